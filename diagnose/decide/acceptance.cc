@@ -61,13 +61,18 @@ double sum_chi2(const std::vector<HoldOutRun>& runs) {
   return sum;
 }
 
-bool is_contradicted(const Selection& selection, const std::vector<HoldOutRun>& judged) {
-  return !are_simulated(judged) || !calc_fall(selection.hold_out_after, judged).is_possible();
+bool is_contradicted(const Selection& selection, const SelectRound& round,
+                     const std::vector<HoldOutRun>& judged) {
+  const std::vector<HoldOutRun>& before = selection.hold_out_after;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (before[i].failure.empty() && !judged[i].failure.empty()) return true;
+  }
+  return !calc_fall(before, judged, round.misfit).is_possible();
 }
 
 bool is_confirmed(const Selection& selection, const SelectRound& round,
                   const std::vector<HoldOutRun>& judged, const SelectOptions& options) {
-  if (is_contradicted(selection, judged)) return false;
+  if (!are_simulated(judged) || is_contradicted(selection, round, judged)) return false;
   const double before = sum_chi2(selection.hold_out_after), fall = before - sum_chi2(judged);
   if (selection.extended.is_dominated) return fall > 0.5 * options.dominated_share * before;
   return round.candidates.front().gain + fall >= round.threshold * round.misfit;
@@ -80,14 +85,16 @@ bool is_near_minimum(const FitResult& calibration, const std::vector<double>& ga
   return calibration.distance * calibration.distance * unit < kSmall * taken;
 }
 
-double calc_rejected_gain(const Selection& selection, const SelectRound& last) {
+Rejected find_rejected(const Selection& selection, const SelectRound& last) {
   constexpr double kLarge = 2.0;  // times the threshold
-  if (last.accepted) return 0.0;
-  if (last.refusal != Refusal::kNone) return last.candidates.front().gain;
+  if (last.accepted) return {};
+  const double first = last.candidates.empty() ? 0.0 : last.candidates.front().gain;
+  if (last.refusal != Refusal::kNone) return {last.refusal, first};
   // A further cause that is too small beside the first would have completed its form.
-  const bool is_further = !last.candidates.empty() && !selection.causes.empty();
-  const double gain = std::max(is_further ? last.candidates.front().gain : 0.0, last.refused_gain);
-  return gain / last.misfit > kLarge * last.threshold ? gain : 0.0;
+  const double further = selection.causes.empty() ? 0.0 : first;
+  const double gain = std::max(further, last.refused_gain);
+  if (gain / last.misfit <= kLarge * last.threshold) return {};
+  return {further >= last.refused_gain ? Refusal::kSmall : Refusal::kImplausible, gain};
 }
 
 }  // namespace strut

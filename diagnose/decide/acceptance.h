@@ -35,9 +35,11 @@ bool is_dispensable(const FitResult& now, double changed, double without);
 /// Sum of chi2 over the held-out runs; larger than any other where one cannot be simulated.
 double sum_chi2(const std::vector<HoldOutRun>& runs);
 
-/// Whether the held-out runs contradict a candidate: from `selection` to `judged`, the same runs
-/// with the candidate, their chi2 rises by more than noise explains, or one cannot be simulated.
-bool is_contradicted(const Selection& selection, const std::vector<HoldOutRun>& judged);
+/// Whether the held-out runs contradict the best candidate: from `selection` to `judged`, the same
+/// runs with the candidate, their chi2 rises by more than noise explains, or one cannot be
+/// simulated any more.
+bool is_contradicted(const Selection& selection, const SelectRound& round,
+                     const std::vector<HoldOutRun>& judged);
 
 /// Whether the held-out runs confirm the best candidate: they do not contradict it, and delta chi2
 /// of all runs exceeds the threshold or, where the model's error dominates, their own chi2 falls by
@@ -49,9 +51,14 @@ bool is_confirmed(const Selection& selection, const SelectRound& round,
 /// less than a twentieth of the causes' delta chi2, the sum of `gains`.
 bool is_near_minimum(const FitResult& calibration, const std::vector<double>& gains);
 
-/// Delta chi2 of the last round that counts as residual: of a candidate that was refused; where it
-/// is large, of one that is too small beside the first cause to be one itself,
-/// or of a fit whose values are not such as its effect has. 0 where there is none.
-double calc_rejected_gain(const Selection& selection, const SelectRound& last);
+/// A candidate of the last round that counts as residual.
+struct Rejected {
+  Refusal reason = Refusal::kNone;
+  double gain = 0.0;  // delta chi2
+};
+
+/// The best candidate if it was refused; where its delta chi2 is large, one that is too small
+/// beside the first cause to be one itself, or a fit whose values are not such as its effect has.
+Rejected find_rejected(const Selection& selection, const SelectRound& last);
 
 }  // namespace strut

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "base/error/check.h"
 #include "base/text/format_number.h"
 #include "diagnose/compare/deciding_noise.h"
 #include "diagnose/decide/acceptance.h"
+#include "diagnose/decide/effect_round.h"
 #include "diagnose/decide/improvement.h"
 #include "diagnose/decide/next_measurement.h"
 #include "diagnose/decide/parameter_changes.h"
@@ -32,10 +34,12 @@ std::optional<UnknownForce> find_force(const CampaignData& data, const DiagnoseO
     selection.causes.clear();
     selection.round_of.clear();
     selection.gains.clear();
+    selection.refusal = Refusal::kNone;
   }
   selection.extended = std::move(found->fit);
   selection.hold_out_after = std::move(found->judged);
-  selection.undetected.clear();  // the map takes their place
+  TestBench bench(data, selection.extended, options.threads);
+  selection.undetected = find_undetected(data, selection.extended, bench);
   const std::string place = found->states.place;
   const ForceMaps maps = list_force_maps_on(data, selection.extended.shared());
   UnknownForce force{
@@ -135,20 +139,23 @@ void add_noise_notes(const CampaignData& data, Diagnosis& diagnosis) {
   }
 }
 
-/// Gives up the causes and the map: the extended model is the calibrated one.
+/// Withdraws the causes and the map: the extended model is the calibrated one, and what they
+/// explained is residual.
 void withdraw(const CampaignData& data, const DiagnoseOptions& options, Diagnosis& diagnosis) {
   Selection& s = diagnosis.selection;
+  const double gain = std::accumulate(s.gains.begin(), s.gains.end(), 0.0);
   s.causes.clear();
   s.round_of.clear();
   s.gains.clear();
   s.extended = s.base;
   s.hold_out_after = s.hold_out_before;
   s.undetected = s.rounds.front().undetected;
-  s.refused.clear();
+  s.refusal = Refusal::kNone;
   diagnosis.force.reset();
   TestBench bench(data, s.base, options.threads);
   s.left = measure_leftover(data, bench);
-  s.is_left = is_significant(s.left);
+  s.left.energy = std::max(s.left.energy, gain);
+  s.is_left = true;
 }
 
 /// Fits the force map, claims what is more probable than a cause outside of the catalogue, and
@@ -167,10 +174,13 @@ void claim(const CampaignData& data, const DiagnoseOptions& options, Diagnosis& 
 void check_improvement(const CampaignData& data, const DiagnoseOptions& options,
                        Diagnosis& diagnosis) {
   if (!diagnosis.is_extended() || is_improved(diagnosis.improvement)) return;
-  diagnosis.notes.push_back(fmt::format("withdrawn, since the held-out runs became worse: {}",
-                                        describe_extension(diagnosis)));
+  const std::string extension = describe_extension(diagnosis);
+  diagnosis.notes.push_back(
+      fmt::format("withdrawn, since the held-out runs became worse: {}", extension));
   diagnosis.verdict.reject(1.0);
   withdraw(data, options, diagnosis);
+  diagnosis.selection.refusal = Refusal::kContradicted;
+  diagnosis.selection.refused = extension;
   for (DiagnosedRun& run : diagnosis.runs) run.after = run.before;
   diagnosis.improvement = calc_improvement(data, diagnosis.selection, diagnosis.runs);
 }

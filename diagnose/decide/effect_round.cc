@@ -356,7 +356,8 @@ SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
   result.misfit = calc_misfit(now.fit, most);
   if (round_options.is_final) {
     result.p_value = nulls.calc_p_value(result.best_score / result.misfit);
-    result.undetected = list_undetected(evidence, one_sided, now.fit.unknowns, result.misfit);
+    result.undetected =
+        list_undetected(evidence, one_sided, now.fit.unknowns, calc_misfit(now.fit, 0.0));
   }
   result.simulations += bench.simulation_count();
   return result;

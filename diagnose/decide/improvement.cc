@@ -10,6 +10,7 @@
 #include "base/parallel/team.h"
 #include "diagnose/baseline/time_windows.h"
 #include "diagnose/campaign/campaign_unknowns.h"
+#include "diagnose/decide/acceptance.h"
 
 namespace strut {
 namespace {
@@ -101,7 +102,8 @@ void fill_likelihood(const Selection& selection, Improvement& improvement) {
   if (!(count > 0.0)) return;
   improvement.log_likelihood_before = before / count;
   improvement.log_likelihood_after = after / count;
-  improvement.hold_out = calc_fall(selection.hold_out_before, selection.hold_out_after);
+  improvement.hold_out = calc_fall(selection.hold_out_before, selection.hold_out_after,
+                                   calc_misfit(selection.extended.fit, 0.0));
 }
 
 }  // namespace

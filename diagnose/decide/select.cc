@@ -14,15 +14,6 @@
 namespace strut {
 namespace {
 
-/// "bump_stop fits the runs for fitting, but ..."; empty where the best candidate was not refused.
-std::string describe_refusal(const SelectRound& round) {
-  if (round.refusal == Refusal::kNone) return "";
-  return round.candidates.front().hypothesis.describe() + " fits the runs for fitting, but " +
-         (round.refusal == Refusal::kContradicted
-              ? "the held-out runs contradict it"
-              : "less well than others where single runs are left out");
-}
-
 class Selector {
  public:
   Selector(const CampaignData& data, const SelectOptions& options)
@@ -55,7 +46,6 @@ class Selector {
       is_last_current_ = !reconsider();
       if (is_last_current_) break;
     }
-    selection_.refused = describe_refusal(last_);
     measure_left();
     return std::move(selection_);
   }
@@ -116,9 +106,15 @@ class Selector {
         is_last_current_ && !last_.accepted ? last_.undetected : find_undetected(data_, now, bench);
     selection_.simulations += bench.simulation_count();
     selection_.is_left = is_significant(selection_.left, options_.leftover);
-    const double rejected = calc_rejected_gain(selection_, last_);
-    if (rejected > 0.0) selection_.is_left = true;
-    selection_.left.energy = std::max(selection_.left.energy, rejected);
+    if (!is_last_current_) return;
+    const Rejected rejected = find_rejected(selection_, last_);
+    if (rejected.reason == Refusal::kNone) return;
+    selection_.is_left = true;
+    selection_.left.energy = std::max(selection_.left.energy, rejected.gain);
+    selection_.refusal = rejected.reason;
+    if (!last_.candidates.empty()) {
+      selection_.refused = last_.candidates.front().hypothesis.describe();
+    }
   }
 
   /// One round, or two; whether causes were added.
@@ -350,16 +346,17 @@ class Selector {
     tell("fitting with " + best.hypothesis.describe());
     WhitenedFit fit = fit_extended(e);
     if (ends_at_limit(fit, best.hypothesis)) {
-      round.refused_gain = std::max(round.refused_gain, best.gain);
+      round.refusal = Refusal::kImplausible;
       return false;
     }
     std::vector<HoldOutRun> judged = judge(fit);
     if (confirmation == Confirmation::kAlone &&
         !is_confirmed(selection_, round, judged, options_)) {
-      if (is_contradicted(selection_, judged)) round.refusal = Refusal::kContradicted;
+      if (is_contradicted(selection_, round, judged)) round.refusal = Refusal::kContradicted;
       return false;
     }
     round.accepted = true;
+    round.refusal = Refusal::kNone;
     selection_.extended = std::move(fit);
     selection_.hold_out_after = std::move(judged);
     selection_.causes.push_back(best.hypothesis);

@@ -69,11 +69,13 @@ struct Candidate {
   long simulations = 0;
 };
 
-/// Why the best candidate of a round is not a cause though it exceeds the threshold.
+/// Why something that exceeds the threshold is not a cause.
 enum class Refusal {
   kNone,
   kContradicted,  // by the held-out runs
   kUnstable,      // not among the best without single runs
+  kImplausible,   // fitted values that the effect cannot have
+  kSmall,         // beside the first cause
 };
 
 /// One round of the selection.
@@ -95,13 +97,14 @@ struct SelectRound {
 };
 
 struct Selection {
-  WhitenedFit base, extended;         // without and with the causes
-  std::vector<Hypothesis> causes;     // in the order in which they were found
-  std::vector<std::size_t> round_of;  // index of each cause's round
-  std::vector<double> gains;          // delta chi2 of each cause in its round
-  Leftover left;                      // residual of the extended model
-  bool is_left = false;               // the residual exceeds noise
-  std::string refused;                // words on what was refused beside the causes; empty: nothing
+  WhitenedFit base, extended;          // without and with the causes
+  std::vector<Hypothesis> causes;      // in the order in which they were found
+  std::vector<std::size_t> round_of;   // index of each cause's round
+  std::vector<double> gains;           // delta chi2 of each cause in its round
+  Leftover left;                       // residual of the extended model
+  bool is_left = false;                // the residual exceeds noise
+  Refusal refusal = Refusal::kNone;    // of what exceeds the threshold beside the causes
+  std::string refused;                 // its name
   std::vector<Undetected> undetected;  // effects beside the causes
   std::vector<SelectRound> rounds;     // in the order in which they were made
   std::vector<HoldOutRun> hold_out_before, hold_out_after;

@@ -97,6 +97,24 @@ std::string describe_residual(const Diagnosis& diagnosis) {
                              : fmt::format("acting at {}, at {}", where.place, where.band);
 }
 
+/// "A fits the runs for fitting, but ..."; empty where nothing was refused.
+std::string describe_refusal(const Selection& selection) {
+  const std::string& name = selection.refused;
+  switch (selection.refusal) {
+    case Refusal::kContradicted:
+      return name + " fits the runs for fitting, but the held-out runs contradict it";
+    case Refusal::kUnstable:
+      return name + " fits the runs for fitting, but less well than others without single runs";
+    case Refusal::kImplausible:
+      return "effects of the catalogue fit only with values that they cannot have";
+    case Refusal::kSmall:
+      return name + " fits what remains, but explains too little to be a cause of its own";
+    case Refusal::kNone:
+      break;
+  }
+  return "";
+}
+
 /// " Incomplete: ..." with the channel that remains furthest above its noise.
 std::string describe_remainder(const CampaignData& data, const Diagnosis& diagnosis) {
   std::string text;
@@ -104,7 +122,7 @@ std::string describe_remainder(const CampaignData& data, const Diagnosis& diagno
   const std::string residual = describe_residual(diagnosis);
   if (!residual.empty()) text += residual;
   if (worst != nullptr) text += (text.empty() ? "" : "; ") + describe_misfit(data, *worst);
-  const std::string& refused = diagnosis.selection.refused;
+  const std::string refused = describe_refusal(diagnosis.selection);
   if (!refused.empty()) text += (text.empty() ? "" : "; ") + refused;
   const std::vector<std::string> worsened = list_worsened(data, diagnosis.runs);
   if (!worsened.empty()) text += "; it worsens " + join(worsened, ", ");
@@ -121,8 +139,10 @@ std::string describe_unknown(const CampaignData& data, const Diagnosis& diagnosi
         describe_misfit(data, *find_worst(verdict.misfits)));
   }
   const std::string remainder = describe_remainder(data, diagnosis);
-  const std::string unknown =
-      "Cause: none of the catalogue" + (remainder.empty() ? "" : "; " + remainder) + ".";
+  // Unstable fits do not exclude the catalogue.
+  const bool is_open = diagnosis.selection.refusal == Refusal::kUnstable;
+  const std::string unknown = (is_open ? "Cause: unknown" : "Cause: none of the catalogue") +
+                              (remainder.empty() ? "" : "; " + remainder) + ".";
   return diagnosis.force ? unknown + " " + describe_improvement(diagnosis) : unknown;
 }
 

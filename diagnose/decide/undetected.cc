@@ -15,14 +15,16 @@ struct Component {
 };
 
 void add_components(const Undetected& u, std::size_t i, std::vector<Component>& components) {
-  // Sizes below the first hardly change a score, those above the last disagree with it.
-  constexpr double kMin = 0.3, kRatio = 1.25, kBeyondScore = 4.0, kMax = 12.0;
-  const double max = std::max(kMax, std::abs(u.score) + kBeyondScore);
-  const double prior = u.prior * std::log(kRatio) / std::log(1e4) * (u.one_sided ? 1.0 : 0.5);
-  for (double s = kMin; s < max; s *= kRatio) {
+  // Sizes below the first hardly change a score; far from a score they disagree with it.
+  constexpr double kMin = 0.3, kMax = 12.0, kReach = 6.0, kMaxRatio = 0.25, kMaxStep = 0.5;
+  const double score = std::abs(u.score), max = std::max(kMax, score + kReach);
+  const double prior = u.prior / std::log(1e4) * (u.one_sided ? 1.0 : 0.5);
+  double step = 0.0;
+  for (double s = std::max(kMin, score > kMax ? score - kReach : 0.0); s < max; s += step) {
+    step = std::min(kMaxRatio * s, kMaxStep);
     const auto add = [&](double size) {
       components.push_back(
-          {std::log(prior) + size * u.score - 0.5 * size * size, size * u.shift[i]});
+          {std::log(prior * step / s) + size * u.score - 0.5 * size * size, size * u.shift[i]});
     };
     add(s);
     if (!u.one_sided) add(-s);

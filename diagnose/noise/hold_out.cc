@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "base/error/check.h"
 #include "base/error/input_error.h"
 #include "base/parallel/team.h"
 #include "diagnose/campaign/campaign_unknowns.h"
@@ -39,17 +38,21 @@ std::vector<double> make_start(const std::vector<Unknown>& unknowns, const Share
 
 bool HoldOutFall::is_possible() const {
   constexpr double kSigmas = 3.0;
-  return fall >= std::min(0.0, expected - kSigmas * 2.0 * std::sqrt(expected));
+  return fall >= std::min(0.0, expected - kSigmas * 2.0 * std::sqrt(misfit * expected));
 }
 
-HoldOutFall calc_fall(const std::vector<HoldOutRun>& before, const std::vector<HoldOutRun>& after) {
+HoldOutFall calc_fall(const std::vector<HoldOutRun>& before, const std::vector<HoldOutRun>& after,
+                      double misfit) {
   HoldOutFall sum;
+  sum.misfit = misfit;
   for (std::size_t i = 0; i < before.size(); ++i) {
     const HoldOutRun &b = before[i], &a = after[i];
     if (!b.failure.empty() || !a.failure.empty()) continue;
     sum.fall += b.chi2 - a.chi2;
-    STRUT_CHECK(b.residual.size() == a.residual.size(), "two models of different readings");
-    sum.expected += (b.residual - a.residual).squaredNorm();
+    // An effect may make one of a run's own unknowns, and its prior, one of all runs.
+    const bool are_alike = b.residual.size() == a.residual.size();
+    const auto count = are_alike ? a.residual.size() : static_cast<Eigen::Index>(a.count);
+    sum.expected += (b.residual.head(count) - a.residual.head(count)).squaredNorm();
   }
   return sum;
 }
@@ -103,7 +106,7 @@ HoldOutRun HoldOutJudge::judge_run(std::size_t i, const SharedValues& shared) co
   run.run = runs_[i];
   run.chi2 = fit.chi2;
   run.count = whitener.whitened_count();
-  run.residual = whitened.evaluate(fit.values).residual.head(static_cast<Eigen::Index>(run.count));
+  run.residual = whitened.evaluate(fit.values).residual;
   run.expected = static_cast<double>(run.count) * whitener.get_share(0);
   // Priors weigh what is unknown about the run.
   run.log_likelihood = -0.5 * fit.chi2 - whitener.get_log_determinant(0);

@@ -17,7 +17,7 @@ struct HoldOutRun {
   double log_likelihood = 0.0;
   std::size_t count = 0;       // of whitened readings
   double expected = 0.0;       // chi2 of a perfect model
-  Eigen::VectorXd residual{};  // of the whitened readings
+  Eigen::VectorXd residual{};  // of the whitened readings, then of the priors
 };
 
 /// Fall of the held-out runs' chi2 from one model to another, and its expectation if the other is
@@ -25,14 +25,16 @@ struct HoldOutRun {
 /// not count.
 struct HoldOutFall {
   double fall = 0.0, expected = 0.0;
+  double misfit = 1.0;  // factor on the variance of the noise
 
   /// Whether chi2 does not rise, or only as noise makes it rise where the other model is true: the
-  /// fall's standard deviation is then 2 sqrt(s), and three of them are allowed. Runs that hardly
-  /// respond neither confirm a cause nor contradict it.
+  /// fall's standard deviation is then 2 sqrt(misfit s), and three of them are allowed. Runs that
+  /// hardly respond neither confirm a cause nor contradict it.
   bool is_possible() const;
 };
 
-HoldOutFall calc_fall(const std::vector<HoldOutRun>& before, const std::vector<HoldOutRun>& after);
+HoldOutFall calc_fall(const std::vector<HoldOutRun>& before, const std::vector<HoldOutRun>& after,
+                      double misfit);
 
 /// Validates all models with the same noise, that of the base model: otherwise a model with a
 /// larger response to noise would have the higher likelihood for that alone.

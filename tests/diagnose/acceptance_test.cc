@@ -110,15 +110,23 @@ bool is_confirmed_by(double fall, double expected, double gain = 1e3, bool is_do
 
 TEST_CASE("Held-out runs contradict a cause that makes them worse by more than noise", "[unit]") {
   // True, a cause lowers chi2 by s with the standard deviation 2 sqrt(s): -8 is three of them off.
-  CHECK(is_confirmed_by(-7.9, 4.0));
-  CHECK_FALSE(is_confirmed_by(-8.1, 4.0));
+  const auto is_possible = [](double fall, double expected, double misfit) {
+    return HoldOutFall{fall, expected, misfit}.is_possible();
+  };
+  CHECK(is_possible(-7.9, 4.0, 1.0));
+  CHECK_FALSE(is_possible(-8.1, 4.0, 1.0));
+  CHECK(is_possible(-19.9, 4.0, 4.0));  // of noise that is twice as large
+  CHECK_FALSE(is_possible(-20.1, 4.0, 4.0));
   // The largest rise that noise explains is 9, and runs that respond must not become worse.
-  CHECK(is_confirmed_by(-8.9, 9.0));
-  CHECK_FALSE(is_confirmed_by(-9.1, 9.0));
+  CHECK(is_possible(-8.9, 9.0, 1.0));
+  CHECK_FALSE(is_possible(-9.1, 9.0, 1.0));
+  // A round's misfit of 1.5 makes that 13.5, at s = 13.5.
+  CHECK(is_confirmed_by(-13.4, 13.5));
+  CHECK_FALSE(is_confirmed_by(-13.6, 13.5));
   CHECK(is_confirmed_by(0.1, 60.0));
   CHECK_FALSE(is_confirmed_by(-0.1, 60.0));
   // Without any response they do not decide.
-  CHECK(HoldOutFall{0.0, 0.0}.is_possible());
+  CHECK(is_possible(0.0, 0.0, 1.0));
 }
 
 TEST_CASE("Where the model's error dominates, half of its fraction has to leave the held-out runs",
@@ -139,40 +147,47 @@ TEST_CASE("A held-out run that cannot be simulated confirms nothing", "[unit]") 
   failed.failure = "lost contact";
   CHECK(sum_chi2({make_held_out(3.0), make_held_out(4.0)}) == 7.0);
   CHECK(sum_chi2({make_held_out(3.0), failed}) > 1e200);
-  CHECK(is_contradicted(s, {failed}));
+  CHECK(is_contradicted(s, make_round(1e6), {failed}));
+  // One that could not be simulated before says nothing, but confirms nothing either.
+  Selection before = s;
+  before.hold_out_after = {failed};
+  CHECK_FALSE(is_contradicted(before, make_round(1e6), {failed}));
+  CHECK_FALSE(is_confirmed(before, make_round(1e6), {failed}, SelectOptions{}));
   CHECK_FALSE(is_confirmed(s, make_round(1e6), {failed}, SelectOptions{}));
 }
 
 TEST_CASE("A rejected candidate of twice the threshold is residual of the causes", "[unit]") {
   const Selection s = make_selection_with_cause(1e5);
-  CHECK(calc_rejected_gain(s, make_round(59.9)) == 0.0);
-  CHECK(calc_rejected_gain(s, make_round(60.1)) == 60.1);
+  CHECK(find_rejected(s, make_round(59.9)).gain == 0.0);
+  CHECK(find_rejected(s, make_round(60.1)).gain == 60.1);
   // No cause whose form it would be.
-  CHECK(calc_rejected_gain(make_selection(), make_round(60.1)) == 0.0);
+  CHECK(find_rejected(make_selection(), make_round(60.1)).gain == 0.0);
   SelectRound accepted = make_round(60.1);
   accepted.accepted = true;
-  CHECK(calc_rejected_gain(s, accepted) == 0.0);
+  CHECK(find_rejected(s, accepted).gain == 0.0);
 }
 
 TEST_CASE("A candidate that was refused leaves a residual, whatever its size", "[unit]") {
   SelectRound round = make_round(30.1);
-  CHECK(calc_rejected_gain(make_selection(), round) == 0.0);
+  CHECK(find_rejected(make_selection(), round).gain == 0.0);
   round.refusal = Refusal::kContradicted;
-  CHECK(calc_rejected_gain(make_selection(), round) == 30.1);
-  CHECK(calc_rejected_gain(make_selection_with_cause(1e5), round) == 30.1);
+  CHECK(find_rejected(make_selection(), round).gain == 30.1);
+  CHECK(find_rejected(make_selection_with_cause(1e5), round).gain == 30.1);
+  CHECK(find_rejected(make_selection(), round).reason == Refusal::kContradicted);
 }
 
 TEST_CASE("A fit with values that its effect cannot have shows that something is there", "[unit]") {
   SelectRound round = make_round(20.0);
   round.refused_gain = 59.9;
-  CHECK(calc_rejected_gain(make_selection(), round) == 0.0);
+  CHECK(find_rejected(make_selection(), round).gain == 0.0);
   round.refused_gain = 60.1;
-  CHECK(calc_rejected_gain(make_selection(), round) == 60.1);
-  CHECK(calc_rejected_gain(make_selection_with_cause(1e5), round) == 60.1);
+  CHECK(find_rejected(make_selection(), round).gain == 60.1);
+  CHECK(find_rejected(make_selection_with_cause(1e5), round).gain == 60.1);
+  CHECK(find_rejected(make_selection_with_cause(1e5), round).reason == Refusal::kImplausible);
   round.candidates.clear();
-  CHECK(calc_rejected_gain(make_selection(), round) == 60.1);
+  CHECK(find_rejected(make_selection(), round).gain == 60.1);
   round.misfit = 1.51;
-  CHECK(calc_rejected_gain(make_selection(), round) == 0.0);
+  CHECK(find_rejected(make_selection(), round).gain == 0.0);
 }
 
 TEST_CASE("A calibration may miss its minimum by a twentieth of what the causes take", "[unit]") {

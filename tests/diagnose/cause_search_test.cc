@@ -162,6 +162,60 @@ TEST_CASE("A late recorder is one cause, not one for every sensor", "[unit]") {
   CHECK(fit.widened.sigma[at] < 2e-4);
 }
 
+/// A damper on a crank that is stiffer in rebound than in compression by the fraction 2
+/// `asymmetry`.
+std::string record_damper(double amplitude, double asymmetry, std::uint64_t seed) {
+  constexpr double kRate = 200.0, kDuration = 4.0, kFrequency = 1.5, kDamping = 1000.0;
+  const double omega = 2.0 * std::numbers::pi * kFrequency;
+  std::string text = "t,x,F\n";
+  for (int i = 0; i <= static_cast<int>(kDuration * kRate); ++i) {
+    const double t = i / kRate, v = amplitude * omega * std::cos(omega * t);
+    const double force = kDamping * v * (v > 0.0 ? 1.0 - asymmetry : 1.0 + asymmetry);
+    const double noise = test::calc_test_normal(seed, 0, static_cast<std::uint64_t>(i));
+    text += test::print_number(t) + "," + test::print_number(amplitude * std::sin(omega * t)) +
+            "," + test::print_number(force + noise) + "\n";
+  }
+  return text;
+}
+
+/// Two runs for fitting and one that is held out, each with its own asymmetry.
+Selection diagnose_dampers(double first, double second, double held_out) {
+  const TemporaryFolder folder;
+  folder.write("a.csv", record_damper(0.02, first, 1));
+  folder.write("b.csv", record_damper(0.015, second, 2));
+  folder.write("c.csv", record_damper(0.0175, held_out, 3));
+  folder.write("rig.toml", "type = \"strut_rig\"\nstiffness = 0\ndamping = 1000\n");
+  const CampaignData data = read_campaign_data(
+      folder.write("campaign.toml",
+                   "model = \"rig.toml\"\n[columns]\ntime = { column = \"t\" }\n"
+                   "displacement = { column = \"x\" }\nforce = { column = \"F\", noise = 1.0 }\n"
+                   "[fit]\nfree = [\"damping\"]\n[[run]]\nfile = \"a.csv\"\nuse = \"fit\"\n"
+                   "[[run]]\nfile = \"b.csv\"\nuse = \"fit\"\n[[run]]\nfile = \"c.csv\"\nuse = "
+                   "\"hold_out\"\n"));
+  return select_causes(data, {});
+}
+
+TEST_CASE("An effect that the held-out run contradicts is unknown, not absent", "[unit]") {
+  constexpr double kSmall = 0.004;  // 10 sigma over the two runs
+  const Selection right = diagnose_dampers(kSmall, kSmall, kSmall);
+  REQUIRE(right.causes.size() == 1);
+  CHECK(right.causes.front().effect == "damper_asymmetry");
+  CHECK(right.refusal == Refusal::kNone);
+  const Selection opposite = diagnose_dampers(kSmall, kSmall, -kSmall);
+  CHECK(opposite.causes.empty());
+  CHECK(opposite.refusal == Refusal::kContradicted);
+  CHECK(opposite.refused == "damper_asymmetry");
+  CHECK(opposite.is_left);
+  CHECK(opposite.left.energy > 20.0);
+}
+
+TEST_CASE("An effect of one run alone is unknown, not absent", "[unit]") {
+  const Selection once = diagnose_dampers(0.006, -0.0015, 0.0);
+  CHECK(once.causes.empty());
+  CHECK(once.refusal != Refusal::kNone);
+  CHECK(once.is_left);
+}
+
 TEST_CASE("A right effect of the model file is left alone", "[unit]") {
   const TemporaryFolder folder;
   const CampaignData data = read_corner(
@@ -282,6 +336,9 @@ Selection find_friction_behind_play(const CampaignData& data, double force_toler
   Selection selection = select_causes(data, options);
   CHECK(has_cause(selection, {"joint_play"}));
   CHECK(has_cause(selection, {"strut_friction"}));
+  // Of the final model, whose causes are parameters, too.
+  REQUIRE_FALSE(selection.undetected.empty());
+  CHECK(selection.undetected.front().shift.size() == selection.extended.shared_count);
   CHECK(get_fitted(selection, "joint_play") == Approx(4e-3).epsilon(tolerance(0.2)));
   CHECK(get_fitted(selection, "strut_friction_force") ==
         Approx(400.0).epsilon(tolerance(force_tolerance)));

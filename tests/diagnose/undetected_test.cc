@@ -86,9 +86,9 @@ TEST_CASE("The averaged interval is that of the integral over sizes", "[unit]") 
 TEST_CASE("An effect of any score moves an interval by what it is likely to be", "[unit]") {
   for (const double score : {12.0, 72.0, 300.0, 1e4}) {
     const Interval i = calc_averaged_interval(0.0, 1.0, 0, {{1.0, score, true, {0.5}}});
-    // Its size is known within 1, and within half a step of the grid.
-    CHECK(i.high > 0.5 * score * 0.85);
-    CHECK(i.high < 0.5 * score * 1.13 + 3.0);
+    // Its size is known within 1, in addition to the value itself.
+    const double expected = 0.5 * score + kNormal95 * std::hypot(1.0, 0.5);
+    CHECK(i.high == Approx(expected).margin(tolerance(0.15)));
     CHECK(i.low == Approx(-kNormal95).epsilon(tolerance(1e-9)));
   }
 }

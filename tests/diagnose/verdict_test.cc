@@ -409,13 +409,31 @@ TEST_CASE("An unknown cause is described by what was refused and by a residual t
   Diagnosis d;
   d.verdict.kind = VerdictKind::kUnknown;
   d.selection.is_left = true;
-  d.selection.refused = "bump_stop fits the runs for fitting, but the held-out runs contradict it";
+  d.selection.refusal = Refusal::kContradicted;
+  d.selection.refused = "bump_stop";
   d.where.band = "9 to 10 Hz";  // of the residual's largest part, which is noise
   CHECK(write_sentence(get_campaign(), d) ==
         "Cause: none of the catalogue; bump_stop fits the runs for fitting, but the held-out runs "
         "contradict it.");
   d.selection.left.significance = 6.1;
   CHECK_THAT(write_sentence(get_campaign(), d), Contains("catalogue; at 9 to 10 Hz; bump_stop"));
+  d.selection.refusal = Refusal::kUnstable;
+  CHECK_THAT(write_sentence(get_campaign(), d), Contains("Cause: unknown; at"));
+}
+
+TEST_CASE("Every sentence on something that remains says what", "[unit]") {
+  for (const Refusal refusal :
+       {Refusal::kContradicted, Refusal::kUnstable, Refusal::kImplausible, Refusal::kSmall}) {
+    Diagnosis d;
+    d.verdict.kind = VerdictKind::kFormIncomplete;
+    CausePosition position;
+    position.candidates = {{"bump_stop", "", 0.98, 9.0, {}}};
+    d.verdict.positions = {position};
+    d.selection.is_left = true;
+    d.selection.refusal = refusal;
+    d.selection.refused = "damper_fade";
+    CHECK_THAT(write_sentence(get_campaign(), d), Contains("Incomplete: ") && Contains(" fit"));
+  }
 }
 
 TEST_CASE("A channel that an extension worsens is told", "[unit]") {
