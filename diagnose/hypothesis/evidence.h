@@ -51,7 +51,7 @@ struct Score {
 /// The score over the runs, run i weighted by `weights[i]`.
 Score calc_score(const Evidence& evidence, const std::vector<double>& weights);
 
-/// Whether the readings tell a column from the adjustable parameters.
+/// Whether the readings distinguish a column from the adjustable parameters.
 bool is_seen(const Score& score, Eigen::Index column);
 
 /// The delta chi2 of these columns; 0 where their best amplitude has the wrong sign (`one_sided`),

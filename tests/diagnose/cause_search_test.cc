@@ -179,7 +179,8 @@ std::string record_damper(double amplitude, double asymmetry, std::uint64_t seed
 }
 
 /// Two runs for fitting and one that is held out, each with its own asymmetry.
-Selection diagnose_dampers(double first, double second, double held_out) {
+Selection diagnose_dampers(double first, double second, double held_out,
+                           const SelectOptions& options = {}) {
   const TemporaryFolder folder;
   folder.write("a.csv", record_damper(0.02, first, 1));
   folder.write("b.csv", record_damper(0.015, second, 2));
@@ -192,7 +193,7 @@ Selection diagnose_dampers(double first, double second, double held_out) {
                    "[fit]\nfree = [\"damping\"]\n[[run]]\nfile = \"a.csv\"\nuse = \"fit\"\n"
                    "[[run]]\nfile = \"b.csv\"\nuse = \"fit\"\n[[run]]\nfile = \"c.csv\"\nuse = "
                    "\"hold_out\"\n"));
-  return select_causes(data, {});
+  return select_causes(data, options);
 }
 
 TEST_CASE("An effect that the held-out run contradicts is unknown, not absent", "[unit]") {
@@ -209,11 +210,15 @@ TEST_CASE("An effect that the held-out run contradicts is unknown, not absent", 
   CHECK(opposite.left.energy > 20.0);
 }
 
-TEST_CASE("An effect of one run alone is unknown, not absent", "[unit]") {
-  const Selection once = diagnose_dampers(0.006, -0.0015, 0.0);
-  CHECK(once.causes.empty());
-  CHECK(once.refusal != Refusal::kNone);
-  CHECK(once.is_left);
+TEST_CASE("An effect that is not stable enough is unknown, not absent", "[unit]") {
+  SelectOptions options;
+  options.stability = 1.1;  // more than any effect has
+  options.certain = 1e9;    // none is exempt
+  const Selection unstable = diagnose_dampers(0.004, 0.004, 0.004, options);
+  CHECK(unstable.causes.empty());
+  CHECK(unstable.refusal == Refusal::kUnstable);
+  CHECK(unstable.refused == "damper_asymmetry");
+  CHECK(unstable.is_left);
 }
 
 TEST_CASE("A right effect of the model file is left alone", "[unit]") {
@@ -336,7 +341,7 @@ Selection find_friction_behind_play(const CampaignData& data, double force_toler
   Selection selection = select_causes(data, options);
   CHECK(has_cause(selection, {"joint_play"}));
   CHECK(has_cause(selection, {"strut_friction"}));
-  // Of the final model, whose causes are parameters, too.
+  // They are beside the final model, whose causes have parameters, too.
   REQUIRE_FALSE(selection.undetected.empty());
   CHECK(selection.undetected.front().shift.size() == selection.extended.shared_count);
   CHECK(get_fitted(selection, "joint_play") == Approx(4e-3).epsilon(tolerance(0.2)));

@@ -1,4 +1,4 @@
-// What effects too small to be detected, and forces of unknown form, leave open.
+// Intervals that allow for effects too small to be detected and for forces of unknown form.
 #include "diagnose/decide/undetected.h"
 
 #include <Eigen/Dense>
@@ -14,7 +14,7 @@ namespace {
 
 using test::tolerance;
 
-constexpr double kMost = 12.0, kLeast = 0.3;  // sizes that count, in standard deviations
+constexpr double kMax = 12.0, kMin = 0.3;  // sizes that count, in standard deviations
 
 TEST_CASE("Without effects an interval is 1.96 standard errors to each side", "[unit]") {
   const Interval i = calc_averaged_interval(5.0, 2.0, 0, {});
@@ -48,10 +48,10 @@ double integrate_quantile(const std::vector<Undetected>& effects, double p) {
     }
   };
   add(1.0, 0.0);
-  const double step = std::log(kLast / kLeast) / kSizes;
+  const double step = std::log(kLast / kMin) / kSizes;
   for (const Undetected& u : effects) {
     for (int k = 0; k < kSizes; ++k) {
-      const double s = kLeast * std::exp((k + 0.5) * step);
+      const double s = kMin * std::exp((k + 0.5) * step);
       const double weight = u.prior * step / std::log(1e4);
       for (const double size : {s, -s}) {
         if (u.one_sided && size < 0.0) continue;
@@ -97,14 +97,14 @@ TEST_CASE("An effect of any score moves an interval by what it is likely to be",
 TEST_CASE("Averaged intervals hold 95 % over all effects that may act", "[unit][statistical]") {
   constexpr int kDraws = 4000;
   constexpr double kShift = 3.0;  // standard errors per standard deviation of the effect
-  const double acts = std::log(kMost / kLeast) / std::log(1e4);
+  const double acts = std::log(kMax / kMin) / std::log(1e4);
   int held = 0, held_plain = 0, effects = 0;
   for (int i = 0; i < kDraws; ++i) {
     const auto uniform = [&](int k) {
       return calc_uniform(7, static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(k));
     };
     const bool is_there = uniform(0) < acts / (1.0 + acts);
-    const double s = is_there ? kLeast * std::pow(kMost / kLeast, uniform(1)) : 0.0;
+    const double s = is_there ? kMin * std::pow(kMax / kMin, uniform(1)) : 0.0;
     const double score = s + calc_normal(8, static_cast<std::uint64_t>(i), 0);
     const double error = -s * kShift + calc_normal(8, static_cast<std::uint64_t>(i), 1);
     const Interval x = calc_averaged_interval(error, 1.0, 0, {{1.0, score, true, {kShift}}});
