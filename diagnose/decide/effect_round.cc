@@ -280,11 +280,6 @@ std::vector<Fitted> fit_ranked(const Round& round, const std::vector<RankedTrial
   return fitted;
 }
 
-std::vector<Hypothesis> list_hypotheses_on(const CampaignData& data, const WhitenedFit& now) {
-  const SharedValues shared = now.shared();
-  return list_hypotheses(data, shared, list_effects_on(data, shared), shared.unknowns);
-}
-
 std::vector<bool> list_one_sided(const CampaignData& data,
                                  const std::vector<Hypothesis>& hypotheses) {
   std::vector<bool> one_sided;
@@ -320,7 +315,7 @@ double calc_negligible(bool has_inputs, const SelectOptions& options, const Whit
 SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
                          const SelectOptions& options, const RoundOptions& round_options) {
   TestBench bench(data, now, options.threads);
-  const std::vector<Hypothesis> hypotheses = list_hypotheses_on(data, now);
+  const std::vector<Hypothesis> hypotheses = list_hypotheses(data, now.shared());
   const std::vector<bool> one_sided = list_one_sided(data, hypotheses);
   const Evidence evidence = bench.gather(hypotheses);
   const Score score = calc_score(evidence, std::vector<double>(evidence.run_count(), 1.0));
@@ -365,7 +360,7 @@ SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
 
 std::vector<Undetected> find_undetected(const CampaignData& data, const WhitenedFit& now,
                                         TestBench& bench) {
-  const std::vector<Hypothesis> hypotheses = list_hypotheses_on(data, now);
+  const std::vector<Hypothesis> hypotheses = list_hypotheses(data, now.shared());
   return list_undetected(bench.gather(hypotheses), list_one_sided(data, hypotheses),
                          now.fit.unknowns, calc_misfit(now.fit, 0.0));
 }

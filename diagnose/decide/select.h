@@ -83,8 +83,8 @@ struct SelectRound {
   std::vector<Candidate> candidates;  // best first
   double threshold = 0.0;             // of Candidate::gain
   bool accepted = false;              // the best candidate became a cause
-  Refusal refusal = Refusal::kNone;
-  double misfit = 1.0;  // chi2 over its expectation, by which gains are divided
+  Refusal refusal = Refusal::kNone;   // of the best candidate
+  double misfit = 1.0;                // chi2 over its expectation, by which gains are divided
   /// Delta chi2 of the first candidate and another effect together, where pairs were looked for.
   double pair_gain = 0.0;
   double best_score = 0.0;  // delta chi2 to first order of the best hypothesis

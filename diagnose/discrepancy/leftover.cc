@@ -149,8 +149,7 @@ std::vector<Actor> list_actors(const std::vector<Hypothesis>& hypotheses,
 /// Forces in struts, on the body, from the road; each by the effect that is simplest.
 std::vector<Hypothesis> list_forces(const CampaignData& data, const SharedValues& shared) {
   std::vector<Hypothesis> chosen;
-  for (Hypothesis& h :
-       list_hypotheses(data, shared, list_effects_on(data, shared), shared.unknowns)) {
+  for (Hypothesis& h : list_hypotheses(data, shared)) {
     const bool is_strut = h.effect == "damper_fade" || h.effect == "damper_asymmetry";
     const bool is_other =
         h.effect == "payload" || h.effect == "bump_height" || h.effect == "bump_length";

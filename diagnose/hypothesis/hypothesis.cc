@@ -244,9 +244,9 @@ EffectSettings list_effects_on(const CampaignData& data, const SharedValues& sha
   return set_unknowns(data.runs[0], shared.unknowns, shared.values).setup.effects();
 }
 
-std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedValues& shared,
-                                        const EffectSettings& model_effects,
-                                        const std::vector<Unknown>& free) {
+std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedValues& shared) {
+  const EffectSettings model_effects = list_effects_on(data, shared);
+  const std::vector<Unknown>& free = shared.unknowns;
   const std::map<std::string, StrutMotion> motions = measure_motion(data, shared);
   const ModelInfo& model = data.model();
   std::vector<Hypothesis> list;

@@ -66,12 +66,11 @@ bool is_one_sided(const CampaignData& data, const Hypothesis& h);
 std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h);
 
 /// Lists the hypotheses that exist in the campaign's model, except those that the campaign excludes
-/// and those with a parameter among `free`. An effect that `model_effects` switches on may be
-/// changed at its place; it may not be added at an overlapping one. Start values are fractions of
-/// the struts' forces, deflections and velocities in the runs for fitting, simulated at `shared`.
-std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedValues& shared,
-                                        const EffectSettings& model_effects,
-                                        const std::vector<Unknown>& free = {});
+/// and those with a parameter among the unknowns of `shared`. An effect that is on
+/// (list_effects_on) may be changed at its place; it may not be added at an overlapping one. Start
+/// values are fractions of the struts' forces, deflections and velocities in the runs for fitting,
+/// simulated at `shared`.
+std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedValues& shared);
 
 /// Whether these values are plausible: no switching parameter is at the limit of its range, where
 /// a fit would leave it, nor a shape at the low end of its search; of a car every one is within ten

@@ -39,8 +39,7 @@ std::string find_refusal(const std::string& effects) {
 
 bool is_listed(const CampaignData& data, const std::string& effect) {
   const Baseline baseline = calibrate_baseline(data);
-  const std::vector<Hypothesis> list =
-      list_hypotheses(data, baseline.calibrated, {}, baseline.calibrated.unknowns);
+  const std::vector<Hypothesis> list = list_hypotheses(data, baseline.calibrated);
   return std::any_of(list.begin(), list.end(),
                      [&](const Hypothesis& h) { return h.effect == effect; });
 }

@@ -64,8 +64,7 @@ const Hypothesis& find_hypothesis(const std::vector<Hypothesis>& list, const std
 }
 
 std::vector<Hypothesis> list_all(const CampaignData& data, const WhitenedFit& fit) {
-  const SharedValues shared = fit.shared();
-  return list_hypotheses(data, shared, list_effects_on(data, shared), shared.unknowns);
+  return list_hypotheses(data, fit.shared());
 }
 
 /// A corner with friction, and its fit without.
@@ -178,21 +177,33 @@ std::string record_damper(double amplitude, double asymmetry, std::uint64_t seed
   return text;
 }
 
+/// A strut rig's campaign of two runs for fitting and one that is held out. `noise`: more keys of
+/// the force's column.
+CampaignData read_three_runs(const TemporaryFolder& folder, const std::vector<std::string>& records,
+                             const std::string& noise, const std::string& free) {
+  folder.write("a.csv", records[0]);
+  folder.write("b.csv", records[1]);
+  folder.write("c.csv", records[2]);
+  folder.write("rig.toml", "type = \"strut_rig\"\nstiffness = 0\ndamping = 1000\n");
+  return read_campaign_data(
+      folder.write("campaign.toml",
+                   "model = \"rig.toml\"\n[columns]\ntime = { column = \"t\" }\n"
+                   "displacement = { column = \"x\" }\nforce = { column = \"F\"" +
+                       noise + " }\n[fit]\nfree = [" + free +
+                       "]\n[[run]]\nfile = \"a.csv\"\nuse = \"fit\"\n"
+                       "[[run]]\nfile = \"b.csv\"\nuse = \"fit\"\n[[run]]\nfile = \"c.csv\"\nuse = "
+                       "\"hold_out\"\n"));
+}
+
 /// Two runs for fitting and one that is held out, each with its own asymmetry.
 Selection diagnose_dampers(double first, double second, double held_out,
                            const SelectOptions& options = {}) {
   const TemporaryFolder folder;
-  folder.write("a.csv", record_damper(0.02, first, 1));
-  folder.write("b.csv", record_damper(0.015, second, 2));
-  folder.write("c.csv", record_damper(0.0175, held_out, 3));
-  folder.write("rig.toml", "type = \"strut_rig\"\nstiffness = 0\ndamping = 1000\n");
-  const CampaignData data = read_campaign_data(
-      folder.write("campaign.toml",
-                   "model = \"rig.toml\"\n[columns]\ntime = { column = \"t\" }\n"
-                   "displacement = { column = \"x\" }\nforce = { column = \"F\", noise = 1.0 }\n"
-                   "[fit]\nfree = [\"damping\"]\n[[run]]\nfile = \"a.csv\"\nuse = \"fit\"\n"
-                   "[[run]]\nfile = \"b.csv\"\nuse = \"fit\"\n[[run]]\nfile = \"c.csv\"\nuse = "
-                   "\"hold_out\"\n"));
+  const CampaignData data =
+      read_three_runs(folder,
+                      {record_damper(0.02, first, 1), record_damper(0.015, second, 2),
+                       record_damper(0.0175, held_out, 3)},
+                      ", noise = 1.0", "\"damping\"");
   return select_causes(data, options);
 }
 
@@ -253,19 +264,10 @@ std::string record_series(double amplitude, double frequency, std::uint64_t seed
 }
 
 CampaignData read_series(const TemporaryFolder& folder, const std::string& free = "\"damping\"") {
-  folder.write("a.csv", record_series(0.02, 1.0, 1));
-  folder.write("b.csv", record_series(0.01, 2.0, 2));
-  folder.write("c.csv", record_series(0.015, 1.5, 3));
-  folder.write("rig.toml", "type = \"strut_rig\"\nstiffness = 0\ndamping = 1000\n");
-  return read_campaign_data(
-      folder.write("campaign.toml",
-                   "model = \"rig.toml\"\n[columns]\ntime = { column = \"t\" }\n"
-                   "displacement = { column = \"x\" }\nforce = { column = \"F\" }\n"
-                   "[fit]\nfree = [" +
-                       free +
-                       "]\n[[run]]\nfile = \"a.csv\"\nuse = \"fit\"\n"
-                       "[[run]]\nfile = \"b.csv\"\nuse = \"fit\"\n[[run]]\nfile = \"c.csv\"\nuse = "
-                       "\"hold_out\"\n"));
+  return read_three_runs(
+      folder,
+      {record_series(0.02, 1.0, 1), record_series(0.01, 2.0, 2), record_series(0.015, 1.5, 3)}, "",
+      free);
 }
 
 bool has_cause(const Selection& selection, const std::vector<std::string>& effects) {

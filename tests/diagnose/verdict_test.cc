@@ -372,6 +372,17 @@ DiagnosedRun make_run(double before, double after) {
   return run;
 }
 
+/// A verdict that claims a bump stop.
+Diagnosis make_claimed(VerdictKind kind) {
+  Diagnosis d;
+  d.verdict.kind = kind;
+  CausePosition position;
+  position.candidates = {{"bump_stop", "", 0.98, 9.0, {}}};
+  position.unknown = d.verdict.unknown_share = 0.02;
+  d.verdict.positions = {position};
+  return d;
+}
+
 TEST_CASE("The stated improvement is the measured one", "[unit]") {
   Selection s;
   const int channel = get_campaign().channels(1).front().channel;
@@ -381,23 +392,14 @@ TEST_CASE("The stated improvement is the measured one", "[unit]") {
   REQUIRE(i.explained);
   CHECK(*i.explained == Approx(0.75).epsilon(tolerance(1e-9)));
   CHECK(i.channels.front().rms_after == Approx(floor + 0.5).epsilon(tolerance(1e-12)));
-  Diagnosis d;
+  Diagnosis d = make_claimed(VerdictKind::kNamed);
   d.improvement = i;
-  d.verdict.kind = VerdictKind::kNamed;
-  CausePosition position;
-  position.candidates = {{"bump_stop", "", 0.98, 9.0, {}}};
-  position.unknown = d.verdict.unknown_share = 0.02;
-  d.verdict.positions = {position};
   const std::string percent = std::to_string(static_cast<int>(std::lround(100.0 * *i.explained)));
   CHECK_THAT(write_sentence(get_campaign(), d), Contains("removes " + percent + " %"));
 }
 
 TEST_CASE("An extension that lowers the likelihood within noise is said to", "[unit]") {
-  Diagnosis d;
-  d.verdict.kind = VerdictKind::kNamed;
-  CausePosition position;
-  position.candidates = {{"bump_stop", "", 0.98, 9.0, {}}};
-  d.verdict.positions = {position};
+  Diagnosis d = make_claimed(VerdictKind::kNamed);
   d.improvement.explained = 0.75;
   d.improvement.hold_out = {-1.1, 4.0};
   CHECK_THAT(write_sentence(get_campaign(), d),
@@ -424,11 +426,7 @@ TEST_CASE("An unknown cause is described by what was refused and by a residual t
 TEST_CASE("Every sentence on something that remains says what", "[unit]") {
   for (const Refusal refusal :
        {Refusal::kContradicted, Refusal::kUnstable, Refusal::kImplausible, Refusal::kSmall}) {
-    Diagnosis d;
-    d.verdict.kind = VerdictKind::kFormIncomplete;
-    CausePosition position;
-    position.candidates = {{"bump_stop", "", 0.98, 9.0, {}}};
-    d.verdict.positions = {position};
+    Diagnosis d = make_claimed(VerdictKind::kFormIncomplete);
     d.selection.is_left = true;
     d.selection.refusal = refusal;
     d.selection.refused = "damper_fade";
